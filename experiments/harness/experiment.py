@@ -52,6 +52,10 @@ class Axis(Enum):
         self.exact = measure == "work"
         self.unit, self.scale = ("", 1.0) if self.exact else ("ns", 1e9)
 
+    def label_in(self, table: str) -> str:
+        """The label in a table: nothing but queries is asked in an order."""
+        return self.label if self.exact or table == QUERIES_TABLE.name else self.measure
+
 
 def measured_operations(preset: Preset) -> tuple[str, ...]:
     """The operations that a preset has measured."""

@@ -135,9 +135,9 @@ def compact(value: float) -> str:
     return f"{value:g}"
 
 
-def axis_label(axis: Axis) -> str:
-    """What is measured along an axis, with its unit."""
-    return f"{axis.label}, {axis.unit}" if axis.unit else axis.label
+def axis_label(axis: Axis, table: str) -> str:
+    """What is measured of a table along an axis, with its unit."""
+    return ", ".join(filter(None, (axis.label_in(table), axis.unit)))
 
 
 def labeled(axes: Axes) -> list[Line2D]:

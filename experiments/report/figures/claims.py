@@ -73,7 +73,7 @@ def _draw_growth(axes: Axes, curve: Curve, judged: JudgedClaim, axis: Axis) -> N
     found = axis.scale * _summary(curve).clip(lower=1.0 if axis.exact else 0.0)
     axes.vlines(curve.sizes, found["smallest"], found["largest"], color=color, linewidth=1.2)
     axes.plot(curve.sizes, found["center"], "o", color=color)
-    _name(axes, style.axis_label(axis))
+    _name(axes, style.axis_label(axis, judged.claim.table))
     raw, slope = two_digits(verdict.raw_slope), two_digits(verdict.slope)
     slopes = f"slope {raw}" if axis.exact else f"slope {raw}, memory out {slope}"
     axes.set(xscale="log", yscale="log", xlabel=f"{style.VARIABLES[axis.variable]}; {slopes}")

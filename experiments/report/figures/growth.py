@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from experiments.bench_fracture import FIND, SHATTER, VISITED, WAYS
 from experiments.bench_workloads import COMPILED, WORKLOADS
 from experiments.claims import MIXES, break_even, curves
-from experiments.harness import ANSWERING, Axis
+from experiments.harness import ANSWERING, QUERIES_TABLE, Axis
 from experiments.report import style
 from experiments.report.comparisons import medians
 from experiments.report.session import require
@@ -103,7 +103,7 @@ def scaling(run: Run, axis: Axis, subjects: Iterable[str] = QUERIES) -> Plot:
     """
     titles = {name: style.TITLES[name] for name in subjects}
     shape: dict[str, Any] = {"diagonals": True, "sharex": True, "sharey": True}
-    label = style.axis_label(axis)
+    label = style.axis_label(axis, QUERIES_TABLE.name)
     if axis is Axis.TIME_FACES and titles.keys() <= QUERIES.keys():
         axis, shape["also"] = Axis.RANDOM_FACES, partial(_draw_order_and_latency, run)
         label = f"time, {axis.unit}"
@@ -153,7 +153,9 @@ def listings(run: Run, axis: Axis = Axis.WORK_FACES) -> Plot:
     """What the thesis' listings cost as published and as corrected: a panel each, against size."""
     table = tables()["listings"]
     costs = _costs(run, axis, table.subjects, table.name)
-    label, scale = (axis.label, 1.0) if axis.exact else (f"{axis.label}, µs", 1e-3)
+    label, scale = axis.label_in(table.name), 1.0
+    if not axis.exact:
+        label, scale = f"{label}, µs", 1e-3
     costs = costs.assign(cost=scale * costs["cost"])
     shape: dict[str, Any] = {"room": 0.45, "columns": 4, "size": (2.75, 2.7), "plain": True}
     return draw(costs, table.subjects, "faces", "the thesis' listings", label, **shape)

@@ -7,8 +7,10 @@ from xml.etree import ElementTree
 import pytest
 
 from experiments.claims import MEMORY, judge_run, load_claims, sentence_claims
+from experiments.harness import Axis
 from experiments.report import pages
 from experiments.report.figures import claims as figures
+from experiments.report.figures import growth
 from experiments.report.session import Session, claim_file
 from experiments.runs import load
 from tests.experiments.made_runs import SIZES, rewrite, write_run
@@ -80,6 +82,17 @@ def test_bytes_are_given_by_field(session, claims):
 def test_a_cell_has_a_panel_for_each_of_its_verdicts(session, claims, key, count):
     figure = figures.draw(session, claims[key])
     assert len(claims[key].verdicts) == len(figure.axes) == count
+
+
+def test_nothing_but_a_query_is_said_to_be_timed_in_an_order(session, claims):
+    for key, told in (("half_edge/vertex_faces", True), ("half_edge/split_edge", False)):
+        titles = [axes.get_title("left") for axes in figures.draw(session, claims[key]).axes]
+        assert ("time in order, ns" in titles, titles.count("time, ns")) == (told, 2 - told)
+        page = pages.browser(session)
+        entry = page[page.index(f'id="{key}"') :].partition("</details>")[0]
+        assert ("time in order by n_t" in entry) == told
+    figure = growth.listings(session.run, Axis.TIME_FACES)
+    assert {it.get_ylabel() for it in figure.axes} == {"", "time, µs"}
 
 
 def test_every_measured_claim_has_a_figure_that_is_whole(session, tmp_path):
