@@ -160,12 +160,19 @@ def face_finding(run: Run) -> Html:
 
 
 def overtaking(table: pd.DataFrame) -> Html:
-    """After how many queries or edits a structure has repaid its building, on the largest mesh."""
-    rows = []
-    for subject, structure, n, times in at_largest(table, "subject").to_numpy():
-        until = "never" if times == np.inf else digits(times)
-        rows.append((MIXES[subject], REGISTRY[structure].title, n, until))
-    return numbers(rows, {"": str, "structure": str, "vertices": count, "until repaid": str})
+    """After how many queries or edits each structure has repaid its building, on the largest mesh.
+
+    A column per query or edit.
+    """
+    largest = at_largest(table, "subject")
+    times = largest.pivot_table("times", "structure", ["subject", "vertices"], sort=False)
+    rows = [(REGISTRY[str(name)].title, *each) for name, each in times.T.items()]
+    heads = [f"{MIXES[subject]}, {size:,} vertices" for subject, size in times]
+    return numbers(rows, {"until repaid": str, **dict.fromkeys(heads, _until)})
+
+
+def _until(times: float) -> str:
+    return "never" if times == np.inf else digits(times)
 
 
 def _slope(verdict: Verdict) -> str:

@@ -189,8 +189,9 @@ def numbers(rows: Iterable[Sequence[Any]], heads: Heads) -> Html:
 
 
 def frame_table(frame: pd.DataFrame) -> Html:
-    """A table of what is text already. Raises MissingError where there is no row."""
-    return numbers(frame.to_numpy(), dict.fromkeys(frame.columns, str))
+    """A table of what is text already, which stands on the left. MissingError: there is no row."""
+    session.require(len(frame), "measured what would stand here")
+    return part("words", list(frame), frame.to_numpy().tolist(), "")
 
 
 class Answer:

@@ -10,10 +10,19 @@ import pytest
 from rich.console import Console
 
 from experiments.bench_workloads import COMPILED, FROM_PYTHON
-from experiments.claims import CLAIMED, Kind, Outcome, break_even, class_told, curves, judge_run
+from experiments.claims import (
+    CLAIMED,
+    MIXES,
+    Kind,
+    Outcome,
+    break_even,
+    class_told,
+    curves,
+    judge_run,
+)
 from experiments.report import comparisons
-from experiments.report.pages import claims_markdown, verdicts
-from experiments.report.session import share
+from experiments.report.pages import claims_markdown, frame_table, numbers, verdicts
+from experiments.report.session import MissingError, share
 from experiments.report.tables import digits, duration, legend, show_claims, tally_rows
 from experiments.report.uses import recommended
 from experiments.runs import load
@@ -156,6 +165,30 @@ def test_times_of_several_machines_are_not_compared(run):
         assert {row[place] for row in apart[1:]} == {"–"}
     assert len(break_even(curves(run)))
     assert break_even(curves(replace(run, meta=several))).empty
+
+
+def test_a_structure_has_a_row_and_every_use_a_column_until_building_is_repaid(run):
+    table = break_even(curves(run))
+    rows = comparisons.overtaking(table).rows
+    titles = {REGISTRY[it].title for it in table["structure"]}
+    assert (len(rows), {row[0] for row in rows[1:]}) == (len(titles) + 1, titles)
+    heads = dict(enumerate(rows[0]))
+    for subject, structure, size, times in table.to_numpy():
+        told = f"{MIXES[subject]}, {size:,} vertices"
+        column = next((at for at, head in heads.items() if head == told), None)
+        (row,) = (it for it in rows if it[0] == REGISTRY[structure].title)
+        if column is not None:
+            assert row[column] == ("never" if times == float("inf") else digits(times))
+    assert len(heads) == 1 + table["subject"].nunique()
+
+
+def test_words_stand_on_the_left_and_numbers_on_the_right():
+    assert 'class="numbers"' in numbers([("one", 1.0)], {"": str, "number": digits})
+    words = frame_table(pd.DataFrame({"at": ["72ce87e"], "claim": ["HEM split_edge"]}))
+    assert 'class="numbers"' not in words
+    assert '<td data-head="claim: ">HEM split_edge</td>' in words
+    with pytest.raises(MissingError):
+        frame_table(pd.DataFrame({"at": []}))
 
 
 def test_work_and_time_of_objects_and_arrays_are_those_of_the_same_mesh(run):
