@@ -202,7 +202,7 @@ def overtaking(run: Run) -> Plot:
 
     def also(axes: Axes, _: str) -> None:
         axes.set_yscale("symlog")
-        axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
+        axes.yaxis.set_major_formatter(lambda value, _: style.compact(value))
         axes.set_ylim(0, 2 * max([1.0, *table["times"]]))
 
     titles = {name: title.capitalize() for name, title in MIXES.items()}

@@ -10,7 +10,7 @@ from matplotlib.colors import TwoSlopeNorm
 
 from experiments.claims import MEMORY
 from experiments.regression import OUTCOMES, ClaimName, Trends
-from experiments.report.style import STYLES, TITLES, Plot, grid, label_ends, styled
+from experiments.report.style import STYLES, TITLES, Plot, grid, label_ends, short_numbers, styled
 from structures import NAMES, REGISTRY
 
 PANELS = {
@@ -38,7 +38,9 @@ def by_commit(trends: Trends, subject: str) -> Plot:
         figure, panels = grid(titles, (5.5, 2.9), 2, Plot, sharex=True)
         for axes, measure in zip(panels, PANELS, strict=True):
             sloped = measure == SLOPE
-            axes.set_yscale("linear" if sloped else "log")
+            if not sloped:
+                axes.set_yscale("log")
+                short_numbers(axes)
             mine = rows[rows["subject"] == (MEMORY if measure == "bytes" else subject)]
             for _, line in mine[mine["measure"] == measure].groupby(["structure", "machine"]):
                 _draw_line(axes, trends, line)
@@ -125,7 +127,7 @@ def departures(trends: Trends) -> Plot:
         for axes, structure in zip(panels, NAMES, strict=True):
             image = _departures(axes, trends, rows[rows["structure"] == structure])
             drawn = axes.imshow(image, cmap="RdBu_r", norm=norm, aspect="auto")
-        bar = figure.colorbar(drawn, ax=panels, shrink=0.5, label=PANELS["time"])
+        bar = figure.colorbar(drawn, ax=panels, shrink=0.5, label="time beside what is usual")
         bar.set_ticks(ticks.tolist(), labels=names)
     return figure
 

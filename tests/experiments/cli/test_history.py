@@ -254,7 +254,10 @@ def test_figures_and_page_are_there_for_any_number_of_runs(base, tmp_path, count
     rings = [it for axes in figure.axes for it in axes.lines if it.get_gid() == "step"]
     crosses = [it for axes in figure.axes for it in axes.lines if it.get_gid() == "verdict"]
     assert bool(rings) == bool(crosses) == (count == 30)
-    history_figures.departures(trends).draw_without_rendering()
+    assert {it.yaxis.get_major_formatter()(1000) for it in figure.axes[1:]} == {"1k"}
+    departures = history_figures.departures(trends)
+    departures.draw_without_rendering()
+    assert departures.axes[-1].get_ylabel() == "time beside what is usual"
     assert ("three at least" in about_history(trends)) == (count < 3)
     assert ("✓ → ✗" in set(history_tables.changes_frame(trends)["before → after"])) == (count == 30)
     page = frame_table(history_tables.runs_frame(trends))

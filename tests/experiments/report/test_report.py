@@ -196,6 +196,12 @@ def test_labels_do_not_overlap_and_stay_inside_the_figure(base_run, name):
             assert not any(box.overlaps(other) for other in boxes[i + 1 :])
 
 
+@pytest.mark.parametrize("name", FIGURES)
+def test_every_plot_writes_a_thousand_alike(base_run, name):
+    for axes in (it for it in FIGURES[name](base_run).axes if it.get_visible()):
+        assert {it.get_major_formatter()(1000) for it in (axes.xaxis, axes.yaxis)} == {"1k"}
+
+
 def test_no_label_lies_over_a_line_that_goes_on():
     with styled():
         plot, (axes,) = panels(["Splits"])
