@@ -1,5 +1,6 @@
 """What counts in real time: single edits as they come, picking, and what a mesh weighs."""
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from experiments.report.figures.growth import draw
 from experiments.report.pages import Heads, Html, numbers, part
 from experiments.report.session import MissingError, require
 from experiments.report.style import BLUE, GRAY, RED, STYLES, Plot
-from experiments.report.tables import count, duration
+from experiments.report.tables import count, digits, duration
 from experiments.runs import Run
 from structures import NAMES, REGISTRY
 
@@ -68,7 +69,7 @@ def frames(run: Run, order: str = GROWING) -> Html:
 
 def compactions(run: Run) -> Html:
     """How long it takes to drop what is dead, at every size."""
-    table = _by_size(_cases(run, COMPACT), "cost")
+    table = _by_size(_cases(run, COMPACT, "how what is dead is dropped"), "cost")
     rows = [(REGISTRY[str(name)].title, *sizes) for name, sizes in table.iterrows()]
     return numbers(rows, {"": str, **{f"{size:,} vertices": duration for size in table}})
 
@@ -143,7 +144,7 @@ def weights(run: Run) -> Html:
         rows.append((family, vertices, faces, *megabytes))
     titles = ["renderer", "render mesh", *(REGISTRY[str(it)].title for it in table)]
     heads: Heads = {"": str, "vertices": count, "faces": count}
-    return numbers(rows, {**heads, **dict.fromkeys(titles, "{:.3g}".format)})
+    return numbers(rows, {**heads, **dict.fromkeys(titles, partial(digits, count=3))})
 
 
 def _told(seconds: Any) -> str:
@@ -161,9 +162,9 @@ def _in_a_frame(seconds: Any) -> str:
     return count(whole.min()) if len(whole) else f"all\N{NO-BREAK SPACE}{count(len(seconds))}"
 
 
-def _cases(run: Run, subject: str) -> pd.DataFrame:
+def _cases(run: Run, subject: str, what: str = "single edits") -> pd.DataFrame:
     mine = medians(run, "bench_real_time").query("subject == @subject")
-    require(len(mine), "measured single edits")
+    require(len(mine), f"measured {what}")
     place = mine["structure"].map(NAMES.index)
     by = ["place", "vertices", "order"]
     return mine.assign(place=place).sort_values(by, ascending=[True, True, False])

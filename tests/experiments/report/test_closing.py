@@ -8,6 +8,7 @@ import pytest
 
 from experiments.claims import JudgedClaim, Outcome, judge_run
 from experiments.harness import Measurement
+from experiments.regression import reduce_run
 from experiments.report import MissingError, about_run, comparisons, pages, uses
 from experiments.report.tables import table_1_in_words
 from experiments.runs import CaseFile, Run, load
@@ -147,3 +148,11 @@ def test_what_was_skipped_of_an_experiment_that_is_gone_is_told_by_its_name(run)
     )
     html = str(about_run(Run(run.folder, run.meta, run.cases, skipped)))
     assert "bench_gone, Indexed: 1 case; too large" in html
+
+
+def test_of_a_baseline_it_is_told_that_the_rest_of_its_run_was_left_out(run):
+    assert "Nothing was skipped" in about_run(run)
+    reduced = reduce_run(run).run
+    told = about_run(reduced)
+    assert f"was kept of this run, {run.folder.name}" in told
+    assert "Nothing was skipped" not in told

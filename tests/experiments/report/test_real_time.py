@@ -1,6 +1,7 @@
 """What the chapter on real time says of single edits."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -86,7 +87,7 @@ def test_a_run_in_which_nothing_around_a_face_was_asked_compiled_says_so(monkeyp
         real_time.picks_in_words(None)
 
 
-@pytest.mark.parametrize("name", ["teapot", "torus:70000"])
+@pytest.mark.parametrize("name", ["teapot", "torus:100", "torus:70000"])
 def test_what_a_mesh_weighs_is_what_its_arrays_do(monkeypatch, name):
     mesh = hem.find_mesh(name)
     s = structures.build("half_edge", mesh)
@@ -95,10 +96,20 @@ def test_what_a_mesh_weighs_is_what_its_arrays_do(monkeypatch, name):
     where = pd.MultiIndex.from_tuples([(name, n, len(mesh.triangles))])
     table = pd.DataFrame({"half_edge": [held]}, index=where)
     monkeypatch.setattr(real_time, "bytes_held", lambda run, width: table)
-    drawn, beside, whole = map(float, real_time.weights(None).rows[1][3:])
+    told = real_time.weights(None).rows[1][3:]
+    assert {len(it.replace(".", "").lstrip("0")) for it in told} == {3}
+    drawn, beside, whole = map(float, told)
     uploaded = np.zeros((n, 3 + 3 + 2), np.float32).nbytes
     indices = render.indices.astype(np.uint16 if n <= 65_536 else np.uint32)
     uploaded += indices.nbytes
     follows = render.points.nbytes + render.indices.nbytes
     expected = np.array([uploaded, follows, uploaded + follows + held]) / 1e6
     assert [drawn, beside, whole] == pytest.approx(expected, rel=5e-3)
+
+
+def test_what_was_not_measured_is_named_as_what_it_is(base_run):
+    cases = base_run.cases[base_run.cases["experiment"] != "bench_real_time"]
+    run = replace(base_run, cases=cases)
+    for show, what in ((real_time.frames, "single edits"), (real_time.compactions, "dead")):
+        with pytest.raises(MissingError, match=what):
+            show(run)
