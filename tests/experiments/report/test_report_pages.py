@@ -202,6 +202,28 @@ def test_the_mark_of_a_claim_stands_on_one_line(front):
     assert len(set(front.run(heights))) == 1
 
 
+def test_on_a_phone_words_of_a_claim_stand_apart_and_beside_its_mark(front):
+    front.size(390)
+    entries = "[...document.querySelectorAll('.entry')]"
+    edge = "it.querySelector('{}').getClientRects()[0].{}"
+    beside = f"{edge.format('.mark', 'right')} <= {edge.format('.what', 'left')}"
+    assert front.run(f"{entries}.filter(it => !({beside})).map(it => it.id)") == []
+    for name in ("who", "outcome"):
+        before = f"getComputedStyle(document.querySelector('.entry .{name}'), '::before').content"
+        assert front.run(before) == '" · "'
+
+
+def test_a_range_and_a_verdict_are_not_broken(chromium, report):
+    chromium.size(1300)
+    chromium.open((report / "half_edge_or_indexed.html").as_uri())
+    lines = "it => { const r = document.createRange(); r.selectNodeContents(it); "
+    lines += "return new Set([...r.getClientRects()].map(it => it.bottom)).size; }"
+    cells = "[...document.querySelectorAll('tr > td:nth-child(n + 3)')]"
+    counts = chromium.run(f"{cells}.filter(it => it.closest('tr').cells.length == 4).map({lines})")
+    assert len(counts) > 40
+    assert set(counts) == {1}
+
+
 def test_search_finds_the_claims_that_have_all_the_words(front):
     every = front.run(KEYS)
     assert search(front, "half-edge collapse")[0] == "half_edge/collapse_edge"
