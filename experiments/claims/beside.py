@@ -54,7 +54,7 @@ def faults_of(m: AsPrinted, about: str = "") -> tuple[Counter[str], str]:
 def require_valid(s: HalfEdgeMesh) -> str:
     """What a mesh has; raises MeshError if it is not sound."""
     s.validate()
-    return f"valid: {s.n_faces} faces, {s.n_edges} edges"
+    return f"valid; faces: {s.n_faces}, edges: {s.n_edges}"
 
 
 def attempt(call: Callable[[], object]) -> str:

@@ -295,13 +295,15 @@ def portraits(peers: Peers) -> Html:
     """How each library's manual has it used, and what it does that ours does not."""
     heads = "Library", "As its manual has it used", "Its manual", "What it does beyond ours"
     others = [PEERS[name] for name in peers.names if name != OURS]
-    rows = (
-        (it.title, _coded(it.manual), it.site.removeprefix("https://"), _coded(it.more))
-        for it in others
-    )
+    rows = ((it.title, _coded(it.manual), _address(it.site), _coded(it.more)) for it in others)
     return page_table([heads, *rows])
 
 
 def _coded(text: str) -> Html:
     """Words for a page, with what stands between backticks as code."""
     return Html(re.sub("`(.+?)`", r"<code>\1</code>", escape(text, quote=False)))
+
+
+def _address(site: str) -> Html:
+    """A link in short, which may go on in the next line after every slash."""
+    return Html("<wbr>").join(it for it in re.split("(?<=/)", site.removeprefix("https://")) if it)

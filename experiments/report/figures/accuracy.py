@@ -11,7 +11,7 @@ from matplotlib.patches import Rectangle
 from experiments.report.style import BLUE, FADED, GRAY, RED, Plot, grid, styled
 from hem.complexity import Curve, Verdict
 
-KINDS = {"right": BLUE, "undetermined": "#d5d5d5", "wrong": RED}
+KINDS = {"right": BLUE, "undetermined": "#b8b8b8", "wrong": RED}
 """What can be said of an answer, and its color in every figure here."""
 
 LEAST_WRITTEN = 0.045  # a share from which on there is room for its number

@@ -131,3 +131,8 @@ def test_where_nothing_was_measured_the_table_says_what_to_run(tmp_path, monkeyp
     monkeypatch.setattr(report_peers, "KEPT", "results/none")
     said = printed("table", "--peers", code=1)
     assert re.search("hem study --peers", " ".join(said.split()))
+
+
+def test_an_address_may_go_on_in_the_next_line_after_a_slash():
+    told = report_peers._address("https://a.org/b/c<d/")
+    assert told == "a.org/<wbr>b/<wbr>c&lt;d/"

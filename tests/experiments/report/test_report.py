@@ -17,6 +17,7 @@ from experiments.claims import CLAIMED
 from experiments.harness import OPERATIONS, Axis
 from experiments.report import Answer, abstract, notebooks, readme, site, uses, write_report
 from experiments.report.figures import growth, memory, meshes
+from experiments.report.figures.accuracy import KINDS
 from experiments.report.pages import page
 from experiments.report.session import share
 from experiments.report.style import GRAY, finish_panels, panels, spread_apart, styled, words
@@ -291,6 +292,13 @@ def test_lines_and_gray_words_stand_out_from_white():
     lines = {it.title: round(contrast(it.look.color), 2) for it in NAMED.values()}
     assert {name: it for name, it in lines.items() if it < 3} == {}
     assert contrast(GRAY) >= 4.5
+
+
+def test_an_open_answer_is_seen_by_day_and_with_colors_inverted_by_night():
+    color = KINDS["undetermined"]
+    inverted = "#" + "".join(f"{255 - round(255 * c):02x}" for c in to_rgb(color))
+    assert contrast(color) > 1.8
+    assert contrast("#17181b") / contrast(inverted) > 1.8
 
 
 def test_the_words_of_the_demo_stand_out_by_day_and_by_night():

@@ -206,6 +206,7 @@ def test_lines_of_the_class_diagram_run_beside_its_boxes_from_who_makes_what_too
         for left, top, width, height in boxes:
             way = np.linspace((x1, y1), (x2, y2), 99) - (left + width / 2, top + height / 2)
             assert not (abs(way) < (width / 2 - 1, height / 2 - 1)).all(axis=1).any()
+    assert shown.rindex("<rect") < shown.index("<circle")  # no box hides the end of a line
     builder, mesh = (boxes[k] for k in (0, 3))
     assert any(y1 == builder[3] + 1 and y2 == mesh[1] for _, _, y1, y2 in lines)
 
