@@ -9,8 +9,9 @@ from typer.testing import CliRunner
 from experiments.claims import judge_run
 from experiments.cli import app
 from experiments.report import notebooks, pdf, site
-from experiments.report.pages import page
+from experiments.report.pages import page, part
 from experiments.report.session import Session, share
+from structures import REGISTRY
 
 installed = pytest.mark.skipif(
     pdf.find_browser() is None,
@@ -70,3 +71,42 @@ def test_the_document_is_printed_with_all_its_claims(document, tmp_path):
     assert content.startswith(b"%PDF-")
     assert b"/Outlines" in content, "bookmarks, as paper has no navigation"
     assert len(re.findall(rb"/Type\s*/Page\b", content)) > 10
+
+
+@installed
+def test_no_table_is_wider_than_its_paper_and_notes_are_smaller_than_words(
+    document, chromium, tmp_path
+):
+    heads = [
+        "",
+        "vertices",
+        "faces",
+        "renderer",
+        "render mesh",
+        *(it.title for it in REGISTRY.values()),
+    ]
+    broad = part(
+        "numbers", heads, [["torus", "1,000,000", "2,000,000", *["0.0587"] * (len(heads) - 3)]]
+    )
+    page = tmp_path / "it.html"
+    page.write_text(document.replace("</main>", f"{broad}</main>"), "utf-8")
+    papers = {
+        "table:not(.slopes)": 210,
+        ".slopes": 594,
+    }  # millimeters, with 14 of them on either side
+    assert "@page broad { size: 594mm 420mm; }" in document
+    chromium.call("Emulation.setEmulatedMedia", media="print")
+    try:
+        for tables, paper in papers.items():
+            chromium.size(round((paper - 28) / 25.4 * 96))
+            chromium.open(page.as_uri())
+            wide = "it => it.scrollWidth > document.documentElement.clientWidth"
+            assert (
+                chromium.run(f"[...document.querySelectorAll('{tables}')].filter({wide}).length")
+                == 0
+            )
+        size = "parseFloat(getComputedStyle(document.querySelector('td{}')).fontSize)"
+        small, words = (chromium.run(size.format(it)) for it in (" small", ""))
+        assert small < words
+    finally:
+        chromium.call("Emulation.setEmulatedMedia", media="")
