@@ -28,9 +28,6 @@ from hem.meshes import position
 
 Point = tuple[float, float, float]
 
-BEYOND = 2.0**128 - 2.0**103
-"""What float32 rounds to infinity, and what is larger."""
-
 
 class Vertex:
     """A position, and one half-edge that leaves it; None as long as no face uses it."""
@@ -48,7 +45,7 @@ class Vertex:
 
     @property
     def point(self) -> Point:
-        """x, y and z. Setting it raises the event, and tells who follows the mesh.
+        """x, y and z, of float32. Setting it raises the event, and tells who follows the mesh.
 
         MeshError for what is no position, which changes nothing.
         """
@@ -56,9 +53,11 @@ class Vertex:
 
     @point.setter
     def point(self, point: Point) -> None:
-        x, y, z = position(point).tolist()
-        if max(abs(x), abs(y), abs(z)) >= BEYOND:
+        with np.errstate(over="ignore"):
+            rounded = position(point).astype(np.float32)
+        if not np.isfinite(rounded).all():
             raise MeshError(f"a position is three finite numbers of float32, not {point!r}")
+        x, y, z = rounded.tolist()
         self._point = x, y, z
         if (event := self.position_changed) is not None:
             try:

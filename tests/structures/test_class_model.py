@@ -241,6 +241,14 @@ def test_a_point_that_is_no_position_moves_nothing(wrong: Any) -> None:
     assert np.array_equal(s.points, before)
 
 
+def test_a_point_that_is_set_is_the_position_that_a_copy_and_a_moved_vertex_have() -> None:
+    s = cast("HalfEdgeMesh", structures.build("half_edge_objects", octahedron()))
+    moved, point = s.copy(), (0.1, 0.2, 0.3)  # none of which is a float32
+    s.vertices[1].point = point
+    moved.move_vertex(1, point)
+    assert s.vertices[1].point == moved.vertices[1].point == s.copy().vertices[1].point
+
+
 def test_a_point_as_large_as_float32_holds_is_a_position() -> None:
     s = cast("HalfEdgeMesh", structures.build("half_edge_objects", octahedron()))
     s.vertices[1].point = (0, 0, np.nextafter(LARGEST + 2.0**103, 0))
