@@ -9,6 +9,8 @@ import pytest
 
 import hem
 import structures
+from hem.authoring import BITS, MARK
+from hem.contract import Navigable
 
 _declared = structures.REGISTRY.items()
 HOLDS_ANYTHING = tuple(name for name, it in _declared if it.searches or it.rebuilds)
@@ -17,6 +19,17 @@ HOLDS_ANYTHING = tuple(name for name, it in _declared if it.searches or it.rebui
 NEEDS_MANIFOLD = tuple(name for name in structures.NAMES if name not in HOLDS_ANYTHING)
 OF_ARRAYS = tuple(name for name in structures.NAMES if structures.REGISTRY[name].fields)
 """Those whose records can be changed at random; the others are made of objects."""
+
+
+WALKED = tuple(name for name, it in _declared if issubclass(it, Navigable))
+"""Where half-edges are recorded, so that an edge has two handles."""
+
+
+def other_name(s: Navigable, edge: int) -> int:
+    """An edge that is not on the border by its other half-edge."""
+    if s.stable_edge_handles:
+        return s.twin(edge)
+    return s.twin(edge >> BITS) << BITS | edge & MARK
 
 
 def octahedron() -> hem.TriangleMesh:

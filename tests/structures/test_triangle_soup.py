@@ -24,11 +24,12 @@ def soup_of(s: Structure) -> Any:
     return s.records.triangle_point[s.faces()].reshape(-1, 3, 3)
 
 
-def test_triangles_meet_where_their_points_do():
+@pytest.mark.parametrize("axis", range(3))
+def test_triangles_meet_where_their_points_do(axis: int):
     s = built()
     v = 7
     f, *others = s.vertex_faces(v).tolist()
-    s.records.triangle_point[f] += 1  # torn off, and called as before
+    s.records.triangle_point[f, axis::3] += 1  # torn off, and called as before
     assert s.vertex_faces(v).tolist() == others
     assert f not in s.face_faces(others[0]).tolist()
     with pytest.raises(hem.MeshError, match="points are where their vertices lie") as broken:

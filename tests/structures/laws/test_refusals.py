@@ -14,7 +14,15 @@ from hem.authoring.kernels import VALENCE
 from hem.contract import QUERIES
 from hem.edit import CHANGED, FACE, VERTEX
 from hem.errors import TopologyError
-from tests.structures.conftest import HOLDS_ANYTHING, NEEDS_MANIFOLD, OF_ARRAYS, octahedron, strip
+from tests.structures.conftest import (
+    HOLDS_ANYTHING,
+    NEEDS_MANIFOLD,
+    OF_ARRAYS,
+    WALKED,
+    octahedron,
+    other_name,
+    strip,
+)
 from tests.structures.histories.actions import faces_of
 from tests.structures.laws.test_operations import TETRAHEDRON
 
@@ -241,19 +249,12 @@ def test_a_batch_is_done_as_a_whole_or_not_at_all(name):
     assert s.collapse_edges([]).tolist() == []
 
 
-@pytest.mark.parametrize(
-    ("name", "other"),
-    [
-        ("half_edge", lambda s, e: int(s.records.half_edge[e, 3])),
-        ("half_edge_objects", lambda s, e: s.half_edges[e].opposite.index),
-        ("plankton", lambda s, e: e + 1),
-    ],
-)
-def test_both_names_of_an_edge_are_one_edge_to_a_batch(name, other):
+@pytest.mark.parametrize("name", WALKED)
+def test_both_names_of_an_edge_are_one_edge_to_a_batch(name):
     s = structures.build(name, octahedron())
     e = int(s.edges()[0])
     with pytest.raises(hem.TopologyError, match="each once"):
-        s.split_edges([e, other(s, e)], np.zeros((2, 3)))
+        s.split_edges([e, other_name(s, e)], np.zeros((2, 3)))
 
 
 def test_a_query_for_what_is_dead_is_refused(name):
