@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
+
 import numpy as np
+import pytest
 
 import hem
 import structures
-from tests.structures.histories.actions import faces_of
+from hem.authoring import VALENCE
+from tests.structures.histories.actions import Aimed, faces_of, surface_of
+from tests.structures.histories.surface import Surface
+from tests.structures.histories.truth import predict
+from tests.structures.laws.test_operations import STARTS
 
 
 def triangles(s: structures.Structure) -> list[tuple[int, ...]]:
@@ -89,3 +96,38 @@ def test_a_moved_vertex_is_moved_and_nothing_else(s):
     points[7] = (1, 2, 3)
     assert np.array_equal(s.points, points)
     assert triangles(s) == before
+
+
+@pytest.mark.parametrize("start", STARTS)
+def test_what_may_be_done_is_at_every_place_what_the_faces_alone_say(name, start):
+    """As built, and where there are splits and holes."""
+    s = structures.build(name, STARTS[start]())
+    for edited in (False, True):
+        if edited:
+            some = s.faces()[::3]
+            s.split_faces(some, np.zeros((len(some), 3)))
+            for face in s.faces()[::4].tolist():
+                with suppress(hem.TopologyError):
+                    s.remove_face(face)
+        m = surface_of(s)
+        for a, b in s.edge_array().tolist():
+            edge = s.find_edge(a, b)
+            assert s.can_flip_edge(edge) == may_be_done(m, "flip_edge", a, b), (a, b)
+            assert s.can_collapse_edge(edge) == may_be_done(m, "collapse_edge", a, b), (a, b)
+        faces = s.faces()
+        told = s.prepare("remove_face", faces).check().tolist()
+        assert told == [may_be_done(m, "remove_face", face) for face in faces.tolist()]
+
+
+def may_be_done(m: Surface, operation: str, *elements: int) -> bool:
+    """Tried on the faces alone, and taken back."""
+    before = m.state()
+    told = predict(m, Aimed(operation, elements, elements[-1]))
+    m.restore(before)
+    return told is not None
+
+
+def test_a_collapse_raises_the_bound_on_the_valence(name):
+    s = structures.build(name, hem.generate("torus", 100))
+    s.collapse_edge(int(s.edges()[0]))
+    assert 6 < s.valence().max() <= s.records.counts[VALENCE]

@@ -203,7 +203,17 @@ def test_no_operation_takes_what_is_left_out_from_the_one_before(name):
 
 @pytest.mark.parametrize(
     "point",
-    [(1, 2), (1, 2, 3, 4), None, "abc", (np.nan, 0, 0), 7, np.inf * np.ones(3), [[1, 2, 3]]],
+    [
+        (1, 2),
+        (1, 2, 3, 4),
+        None,
+        "abc",
+        (np.nan, 0, 0),
+        (0, 0, np.nan),
+        7,
+        np.inf * np.ones(3),
+        [[1, 2, 3]],
+    ],
 )
 def test_what_is_no_position_is_refused(name, point):
     s = structures.build(name, octahedron())
