@@ -167,7 +167,7 @@ def overtaking(table: pd.DataFrame) -> Html:
     largest = at_largest(table, "subject")
     times = largest.pivot_table("times", "structure", ["subject", "vertices"], sort=False)
     rows = [(REGISTRY[str(name)].title, *each) for name, each in times.T.items()]
-    heads = [f"{MIXES[subject]}, {size:,} vertices" for subject, size in times.columns.to_list()]
+    heads = [f"{MIXES[subject]}, {size:,} vertices" for subject, size in map(tuple, times.columns)]
     return numbers(rows, {"until repaid": str, **dict.fromkeys(heads, _until)})
 
 
